@@ -21,16 +21,25 @@ class RefinedProof {
                               const std::function<double(Index)>& limit_at, const std::function<bool(Index)>& is_far);
 
  private:
-  struct Known {
-    ErrorProof::Face face;
-    ErrorProof::Shares shares;
+  // Some faces, with vertices of their own.
+  struct Part {
+    std::vector<Index> faces;  // their numbers in the whole; ascending
+    std::vector<ErrorProof::Corner> corners;
+    std::vector<Triangle> triangles;
+    std::vector<ErrorProof::Shares> shares;
   };
+
+  std::vector<Index> update_corners(const FinishedMesh& mesh, const std::vector<Index>& changed,
+                                    const std::function<double(Index)>& limit_at);
+  std::vector<Index> low_faces(const FinishedMesh& mesh) const;
+  Part part(const FinishedMesh& mesh, std::vector<Index> faces);
 
   ErrorProof proof_;
   const bool bends_at_once_;
   bool is_first_ = true;
   std::vector<ErrorProof::Corner> corners_;  // by vertex
-  std::vector<Known> known_;                 // by face
+  std::vector<ErrorProof::Shares> shares_;   // by face
+  std::vector<Index> number_;                // of every vertex in a part; kNone between calls
 };
 
 }  // namespace vmesh

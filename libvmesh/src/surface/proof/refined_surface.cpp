@@ -18,18 +18,25 @@ constexpr double kLeastGain = 1e-3;  // of skewness
 // at creases, where the triangles that are proven are hard to find, smaller ones are.
 constexpr double kRounder = 0.03, kRounderAtCreases = 1e-3;
 constexpr double kWorthALift = 0.2, kWorthALiftAtCreases = 0.05;
+constexpr double kWorthATry = 0.5;    // of what is worth a move: as much is expected
 constexpr double kLongestMove = 0.3;  // in edges
 constexpr double kRound = 0.5;        // skewness up to which triangles may become worse for the sake of balance
 
 double skewness(const PlacedFace& f) { return equiangle_skewness(f.points[0], f.points[1], f.points[2]); }
 
+struct BestWay {
+  Vec3 way = Vec3::Zero();
+  double gain = 0;  // relative, of energy, as far as two derivatives tell
+};
+
 // One Newton step, no longer than `longest`.
-Vec3 best_way(const PlanarEnergy& shape, const Vec3& u, const Vec3& w, double longest) {
-  if (!std::isfinite(shape.value)) return Vec3::Zero();
+BestWay best_way(const PlanarEnergy& shape, const Vec3& u, const Vec3& w, double longest) {
+  if (!std::isfinite(shape.value)) return {};
   const Eigen::Vector2d step = -shape.hessian.inverse() * shape.gradient;
   const double length = step.norm();
-  if (!std::isfinite(length)) return Vec3::Zero();
-  return std::min(1.0, longest / length) * (step.x() * u + step.y() * w);
+  if (!std::isfinite(length)) return {};
+  const double share = std::min(1.0, longest / length);
+  return {share * (step.x() * u + step.y() * w), -share * (1 - share / 2) * shape.gradient.dot(step) / shape.value};
 }
 
 }  // namespace
@@ -80,13 +87,7 @@ void RefinedSurface::improve(std::vector<Index>& due) {
     sort_unique(faces);
     due.insert(due.end(), faces.begin(), faces.end());
     changed.clear();
-    for (const Index f : faces) {
-      for (const std::size_t k : {0, 1, 2}) {
-        if (!mesh.has_face(f)) continue;
-        const Triangle& face = mesh.faces()[f];
-        flip({face[k], face[(k + 1) % 3]});
-      }
-    }
+    for (const MeshEdge& e : edges_of(faces)) flip(e);
     std::vector<Index> vertices;
     for (const Index f : faces) {
       if (mesh.has_face(f)) vertices.insert(vertices.end(), mesh.faces()[f].begin(), mesh.faces()[f].end());
@@ -99,14 +100,29 @@ void RefinedSurface::improve(std::vector<Index>& due) {
   sort_unique(due);
 }
 
+// Of those of the faces that are there, each once.
+std::vector<MeshEdge> RefinedSurface::edges_of(const std::vector<Index>& faces) const {
+  std::vector<MeshEdge> edges;
+  for (const Index f : faces) {
+    if (!mesh.has_face(f)) continue;
+    for (const MeshEdge& e : edges_of(mesh.faces()[f])) edges.push_back({std::min(e.a, e.b), std::max(e.a, e.b)});
+  }
+  sort_unique(edges);
+  return edges;
+}
+
 void RefinedSurface::flip(const MeshEdge& e) {
   if (!mesh.is_inner(e) || !mesh.may_flip(e)) return;
   const Step step = mesh.flipping(e);
   const auto [c, d] = mesh.opposite(e);
-  const double now = worst_now(step), then = worst_skewness(step), off_now = off_at(e), off_then = off_at({c, d});
-  const bool is_nearer = off_now > kWorthAProof && off_then < 0.7 * off_now && then < kWorstSkewness;
-  const bool is_better = then < now - kLeastGain && off_then < std::max(off_now, 0.7 * kWorthAProof);
-  const bool is_regular = then < kRound && off_then < kWorthAProof * 0.9 && irregularity_after(e, c, d) < 0;
+  const double now = worst_now(step), then = worst_skewness(step), off_now = off_at(e);
+  const bool may_be_nearer = off_now > kWorthAProof && then < kWorstSkewness, may_be_better = then < now - kLeastGain;
+  const bool may_be_regular = then < kRound && irregularity_after(e, c, d) < 0;
+  if (!(may_be_nearer || may_be_better || may_be_regular)) return;
+  const double off_then = off_at({c, d});
+  const bool is_nearer = may_be_nearer && off_then < 0.7 * off_now;
+  const bool is_better = may_be_better && off_then < std::max(off_now, 0.7 * kWorthAProof);
+  const bool is_regular = may_be_regular && off_then < kWorthAProof * 0.9;
   if ((is_nearer || is_better || is_regular) && stays_upright(step, way_.upright)) take({step}, kWorstSkewness);
 }
 
@@ -160,19 +176,21 @@ void RefinedSurface::move(Index v) {
   const bool at_crease = is_at_crease(v);
   const double rounder = at_crease ? kRounderAtCreases : kRounder;
   const double worth_a_lift = at_crease ? kWorthALiftAtCreases : kWorthALift;
+  const bool is_lifted = !crease_at[v] && std::abs(lift - height) > worth_a_lift * most;
+  const bool may_be_lower = crease_at[v] && height > most;
+  const auto [way, gain] = best_way(shape, u, w, kLongestMove * mesh.mean_edge(v));
+  if (gain < kWorthATry * rounder && !is_lifted && !may_be_lower) return;
   const double off_now = off_around(v);
-  const Vec3 way = best_way(shape, u, w, kLongestMove * mesh.mean_edge(v));
   for (const double share : {1.0, 0.5, 0.0}) {
     const Vec3 p = point(v) + share * way;
     const auto on_crease = crease_at[v] ? onto_crease(field_, *crease_at[v], p, limit_at(v)) : std::nullopt;
     if (crease_at[v] && !on_crease) continue;
     const BoundaryPoint target = on_crease ? towards(*on_crease, p, mesh.mean_edge(v))
                                            : onto_boundary(field_, p, cone(v), kRefinedTolerance, lift);
-    const bool is_lower = on_crease && height > most && distance_by_slope(target.sample) < 0.9 * height;
+    const bool is_lower = may_be_lower && distance_by_slope(target.sample) < 0.9 * height;
     const Step step = mesh.moving(v, finished_vertex(target, field_));
     const double worst = std::max(worst_now(step), kRound);
     const bool is_rounder = energy(step) < (1 - rounder) * shape.value;
-    const bool is_lifted = !crease_at[v] && std::abs(lift - height) > worth_a_lift * most;
     if (!(is_rounder || is_lifted || is_lower) || worst_skewness(step) > worst || !stays_upright(step, way_.upright))
       continue;
     if (off_around(v, target.position) > std::max(kWorthAProof * 0.9, off_now)) continue;

@@ -83,6 +83,7 @@ class RefinedSurface {
   void improve(std::vector<Index>& due);
 
  private:
+  std::vector<MeshEdge> edges_of(const std::vector<Index>& faces) const;
   void flip(const MeshEdge& e);
   void move(Index v);
   int irregularity_after(const MeshEdge& e, Index c, Index d) const;
