@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace vmesh {
 namespace {
@@ -10,7 +9,7 @@ namespace {
 // Bound on how much the radius of the touching sphere changes per distance moved: the tangent of the cone's half angle.
 double radius_slope(double first, double last, double length) {
   const double change = std::abs(last - first);
-  if (change >= length) return std::numeric_limits<double>::infinity();
+  if (change >= length) return 0;  // one end contains the other: its sphere touches everywhere
   const double sine = change / length;
   return sine / std::sqrt(1 - sine * sine);
 }

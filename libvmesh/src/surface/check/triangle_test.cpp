@@ -203,11 +203,13 @@ class TriangleTest {
     const TestedCone& cone = *b.cone;
     for (std::size_t k = 0; k < 3; ++k) b.corner_gradient[k] = cone.shape.gradient((*points_)[k], b.at[k].t);
     b.rate = b.bend = b.jump = std::numeric_limits<double>::infinity();
-    const double widening = cone.shape.r1 - cone.shape.r0;
-    if (b.from_center <= 0.5 * reach_ || std::abs(widening) >= cone.length) return;
-    const double sine = widening / cone.length, cosine = std::sqrt(1 - sine * sine);
+    if (b.from_center <= 0.5 * reach_) return;
+    const double sine = cone.is_ball() ? 0 : (cone.shape.r1 - cone.shape.r0) / cone.length;
+    const double cosine = std::sqrt(1 - sine * sine);
     b.rate = 1 / b.from_center;
     b.bend = std::sqrt(4.0 / 3) / (cosine * b.from_center * b.from_center);
+    b.jump = 0;
+    if (cone.is_ball()) return;
     // Where the touching sphere would be on the line of the axis, and by how far it may be off on the triangle.
     const Vec3 away = center_ - cone.first;
     const double along = away.dot(cone.axis) / cone.length, across = away.cross(cone.axis).norm() / cone.length,
@@ -277,8 +279,8 @@ class TriangleTest {
   // the distance moved divided by the cosine of the cone's half angle.
   std::pair<double, double> shares_of(const TestedCone& cone, double t) const {
     const auto [least, most] = std::minmax({cone.first_share, cone.last_share});
-    if (least == most) return {least, most};
     const double share = cone.share_at(t);
+    if (least == most || cone.is_ball()) return {share, share};
     const double change = std::min(std::sqrt(1 + cone.slope * cone.slope) * reach_ / cone.length, 1.0) * (most - least);
     return {std::max(least, share - change), std::min(most, share + change)};
   }
