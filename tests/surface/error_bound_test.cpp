@@ -100,9 +100,23 @@ Outcome try_to_prove(const VesselField& field, int trials, const Draw& draw) {
   return outcome;
 }
 
+// The fifth node's sphere contains that of the sixth, where a thin vessel goes on.
+Centerline vessel_with_knob() {
+  const std::vector<CenterlineNode> nodes = {{{0, 0, 0}, 1.5},
+                                             {{-1.03, -3.87, -1.23}, 1.54},
+                                             {{-0.09, -7.1, -1.95}, 0.78},
+                                             {{0.09, -7.47, -2.12}, 0.85},
+                                             {{0.37, -7.79, -2.4}, 0.985},
+                                             {{0.55, -7.84, -2.31}, 0.24},
+                                             {{1.16, -8, -2}, 0.26},
+                                             {{1.57, -8.08, -1.84}, 0.25}};
+  std::vector<CenterlineSegment> segments;
+  for (Index n = 1; n < nodes.size(); ++n) segments.push_back({n - 1, n});
+  return {nodes, segments};
+}
+
 // What is true with a margin should be proven.
-TEST(ErrorProof, HoldsOnlyWhatDensePointsConfirm) {
-  const Centerline centerline = testing::fork(50);
+void expect_confirmed_and_proven(const Centerline& centerline) {
   for (const double blend : {0.0, 0.5}) {
     const VesselField field(centerline, blend);
     std::mt19937 random(3);
@@ -122,6 +136,10 @@ TEST(ErrorProof, HoldsOnlyWhatDensePointsConfirm) {
     EXPECT_GT(outcome.clear_and_proven, 0.95 * outcome.clear) << "of " << outcome.clear;
   }
 }
+
+TEST(ErrorProof, HoldsOnlyWhatDensePointsConfirm) { expect_confirmed_and_proven(testing::fork(50)); }
+
+TEST(ErrorProof, HoldsOnlyWhatDensePointsConfirmAtAKnob) { expect_confirmed_and_proven(vessel_with_knob()); }
 
 // A vessel that bends by up to `bend` at every node, and widens and narrows.
 Centerline bent_vessel(double bend, std::mt19937& random) {
@@ -208,6 +226,20 @@ TEST(ErrorLimit, IsProvenOnAFork) {
   EXPECT_TRUE(unproven_faces(result.mesh, result.binding, field, options.max_error).empty());
   // The same surface is nowhere near a hundredth of that.
   EXPECT_FALSE(unproven_faces(result.mesh, result.binding, field, parse_error_limit("0.1%")).empty());
+}
+
+// The sphere that is nearest does not change there, however steep the segment.
+TEST(ErrorLimit, IsProvenAtAKnob) {
+  const Centerline centerline = vessel_with_knob();
+  GenerateOptions options;
+  options.blend = 0.5;
+  options.max_error.relative = 0.01;
+  const GenerateResult result = generate_surface(centerline, options);
+  EXPECT_EQ(result.error.unproven_faces, 0u);
+  // Not only by dividing faces on and on.
+  options.max_error = {};
+  options.around = 18;
+  EXPECT_LT(result.mesh.vertices.size(), 2 * generate_surface(centerline, options).mesh.vertices.size());
 }
 
 // At an open end the surface ends, and the boundary does not.

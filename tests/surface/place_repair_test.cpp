@@ -90,7 +90,7 @@ TEST(SurfaceExcerpt, HoldsWhatIsNotToChange) {
 
 // Daughters that part at 12 degrees.
 TEST(PlaceRepair, ProvesWhatRefiningLeaves) {
-  const Centerline fork{{{{0, 0, -3}, 1}, {{0, 0, 0}, 1}, {{1.1, 0, 8}, 0.5}, {{-0.55, 0, 8}, 0.8}},
+  const Centerline fork{{{{0, 0, -3}, 1}, {{0, 0, 0}, 1}, {{1.2, 0, 8}, 0.5}, {{-0.55, 0, 8}, 0.8}},
                         {{0, 1}, {1, 2}, {1, 3}}};
   Study study(fork, 0.05);
   const RefinementGoal goal = goal_of(0.05);
