@@ -3,12 +3,36 @@
 #include <algorithm>
 #include <cmath>
 
+#include "surface/proof/by_slope.h"
+
 namespace vmesh {
 namespace {
 
 // Largest cosine between the gradients of two cones that meet in a crease.
 constexpr double kCrease = 0.9;
 constexpr int kNewtonSteps = 6;
+constexpr double kNearer = 0.3;  // samples on both sides of a kink are taken at this share of the last distance from it
+
+// The plane that a sample tells of.
+struct WallPlane {
+  double distance;  // of p
+  Vec3 normal;
+};
+WallPlane plane_of(const BoundaryPoint& at, const Vec3& p) {
+  const double slope = at.sample.gradient.norm();
+  if (!(slope > 0)) return {0, Vec3::Zero()};
+  const Vec3 normal = at.sample.gradient / slope;
+  return {at.sample.distance / slope + normal.dot(p - at.position), normal};
+}
+
+// Moves p the shortest way to both planes. Returns whether they are planes of two walls.
+bool move_to_both(const WallPlane& a, const WallPlane& b, Vec3& p) {
+  const double cosine = a.normal.dot(b.normal), divisor = 1 - cosine * cosine;
+  if (cosine > kCrease || divisor < 1e-3) return false;
+  p -=
+      (a.distance - cosine * b.distance) / divisor * a.normal + (b.distance - cosine * a.distance) / divisor * b.normal;
+  return true;
+}
 
 }  // namespace
 
@@ -50,6 +74,26 @@ std::optional<BoundaryPoint> onto_crease(const VesselField& field, const Crease&
     if (divisor < 1e-3) return std::nullopt;
     p -= (a.distance - cosine * b.distance) / divisor * a.gradient +
          (b.distance - cosine * a.distance) / divisor * b.gradient;
+  }
+  return std::nullopt;
+}
+
+std::optional<BoundaryPoint> onto_kink(const VesselField& field, const BoundaryPoint& a, const BoundaryPoint& b,
+                                       double limit) {
+  const Vec3 middle = 0.5 * (a.position + b.position);
+  const double reach = (a.position - b.position).norm();
+  BoundaryPoint at_a = a, at_b = b;
+  Vec3 p = middle;
+  double share = 1;
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    if (!move_to_both(plane_of(at_a, p), plane_of(at_b, p), p) || (p - middle).norm() > reach) return std::nullopt;
+    const FieldSample s = field.sample(p, a.sample.cone);
+    if (step > 0 && std::abs(distance_by_slope(s)) < 0.1 * limit) return BoundaryPoint{p, s};
+    share *= kNearer;
+    at_a.position = p + share * (a.position - p);
+    at_b.position = p + share * (b.position - p);
+    at_a.sample = field.sample(at_a.position, a.sample.cone);
+    at_b.sample = field.sample(at_b.position, b.sample.cone);
   }
   return std::nullopt;
 }

@@ -27,4 +27,9 @@ std::vector<Crease> creases_between(const VesselField& field, const CreaseEnd& a
 /// on the boundary.
 std::optional<BoundaryPoint> onto_crease(const VesselField& field, const Crease& crease, Vec3 p, double limit);
 
+/// A point between two of the boundary where it bends sharply although its cones are blended: where one pair of them
+/// takes over from another. Within a tenth of `limit` (mm) of it; nothing if there is none.
+std::optional<BoundaryPoint> onto_kink(const VesselField& field, const BoundaryPoint& a, const BoundaryPoint& b,
+                                       double limit);
+
 }  // namespace vmesh

@@ -46,6 +46,7 @@ RefinedSurface::RefinedSurface(const FinishedSurface& surface, const VesselField
       edit(mesh),
       held(mesh.vertices().size(), 0),
       crease_at(mesh.vertices().size()),
+      at_kink(mesh.vertices().size(), 0),
       has_creases(field.relations().blend() == 0),
       field_(field),
       goal_(goal),
@@ -66,6 +67,7 @@ Index RefinedSurface::take(const std::vector<Step>& steps, double worst) {
 void RefinedSurface::note_faces_around(Index v) {
   held.resize(mesh.vertices().size(), 0);
   crease_at.resize(mesh.vertices().size());
+  at_kink.resize(mesh.vertices().size(), 0);
   const auto& fan = mesh.faces_around(v);
   changed.insert(changed.end(), fan.begin(), fan.end());
 }
@@ -157,7 +159,7 @@ bool RefinedSurface::stays_upright(const Step& step, double least) const {
 
 // To where its triangles have the best shape, as high as balances them.
 void RefinedSurface::move(Index v) {
-  if (!mesh.has_vertex(v) || held[v]) return;
+  if (!mesh.has_vertex(v) || held[v] || at_kink[v]) return;
   double area = 0, sum = 0;
   const double height = lift_of(v);
   PlanarEnergy shape;

@@ -34,6 +34,7 @@ class RefinedSurface {
   GuardedEdit<FinishedVertex> edit;
   std::vector<char> held;                        ///< by vertex: on openings, and others that stay
   std::vector<std::optional<Crease>> crease_at;  ///< of every vertex on one
+  std::vector<char> at_kink;                     ///< by vertex: stays where the boundary bends sharply
   std::vector<Index> changed;                    ///< faces, by the steps of this pass
   const bool has_creases;
 

@@ -166,6 +166,7 @@ class Refinement {
     if (const auto crease = crease_on(e)) {
       if (divide_at(*crease, e)) return;
     }
+    if (way_.at_kinks && divide_at_kink(e)) return;
     std::vector<Step> steps;
     const double lift = surface_.crease_at[e.a] || surface_.crease_at[e.b] || !surface_.is_balanced()
                             ? 0
@@ -182,8 +183,7 @@ class Refinement {
 
   bool divide_at(const CreasePoint& crease, const MeshEdge& e) {
     const BoundaryPoint& at = crease.at;
-    const double share = (at.position - surface_.point(e.a)).dot(surface_.point(e.b) - surface_.point(e.a)) /
-                         (surface_.length(e) * surface_.length(e));
+    const double share = share_along(e, at.position);
     if ((at.position - surface_.middle_of(e)).norm() > surface_.length(e)) {
       if (!way_.descends) return false;
       const BoundaryPoint lower = surface_.towards(at, surface_.middle_of(e), surface_.length(e));
@@ -196,8 +196,38 @@ class Refinement {
            place({surface_.mesh.moving(end, finished_vertex(at, field_))}, crease.crease);
   }
 
-  // Takes the best of the steps by which no triangle turns over.
+  // Where the boundary bends sharply, a vertex is put there and stays.
+  bool divide_at_kink(const MeshEdge& e) {
+    const auto end_at = [&](Index v) {
+      return BoundaryPoint{surface_.point(v), field_.sample(surface_.point(v), surface_.cone(v))};
+    };
+    const auto kink = onto_kink(field_, end_at(e.a), end_at(e.b), surface_.limit_of(e));
+    if (!kink) return false;
+    const FinishedVertex vertex = finished_vertex(*kink, field_);
+    const double share = share_along(e, kink->position);
+    if (share > kNearEnd && share < 1 - kNearEnd) return stays(place({surface_.mesh.splitting(e, vertex)}));
+    const Index end = share <= kNearEnd ? e.a : e.b;
+    return !surface_.held[end] && !surface_.at_kink[end] && stays(place({surface_.mesh.moving(end, vertex)}));
+  }
+
+  bool stays(Index placed) {
+    if (placed != kNone) surface_.at_kink[placed] = 1;
+    return placed != kNone;
+  }
+
+  double share_along(const MeshEdge& e, const Vec3& p) const {
+    const Vec3 &a = surface_.point(e.a), &b = surface_.point(e.b);
+    return (p - a).dot(b - a) / (b - a).squaredNorm();
+  }
+
   bool place(std::vector<Step> steps, const std::optional<Crease>& crease) {
+    const Index placed = place(std::move(steps));
+    if (placed != kNone) surface_.crease_at[placed] = crease;
+    return placed != kNone;
+  }
+
+  // Takes the best of the steps by which no triangle turns over.
+  Index place(std::vector<Step> steps) {
     Index placed = kNone;
     for (const double least : way_.upright_splits) {
       std::vector<Step> upright;
@@ -206,8 +236,7 @@ class Refinement {
       placed = surface_.take(upright, kWorstSkewness);
       if (placed != kNone) break;
     }
-    if (placed != kNone) surface_.crease_at[placed] = crease;
-    return placed != kNone;
+    return placed;
   }
 
   // Where the boundaries of two cones meet, near the middle of an edge that crosses there or runs along.

@@ -14,6 +14,7 @@ struct RefinementWay {
   /// Of the square root of limit times radius, which edges of even surfaces have about three times: no edge becomes
   /// shorter.
   double shortest = 0.3;
+  bool at_kinks = false;  ///< edges are divided where the boundary bends sharply
 };
 
 /// The first is the usual one.
