@@ -133,10 +133,17 @@ class PlaceRepair {
     return true;
   }
 
-  // The usual way of refining every other time.
+  // The usual way of refining every other time, and with rounding often one that knows of kinks.
+  int way_of_try() {
+    if (chance_.below(2) == 0) return 0;
+    const bool at_kinks = field_.relations().blend() > 0 && chance_.below(2) == 0;
+    return at_kinks ? chance_.one_of(kWaysAtKinks)
+                    : static_cast<int>(chance_.below(static_cast<std::size_t>(refinement_ways())));
+  }
+
   RefinementGoal goal_of(const SurfaceExcerpt& excerpt, const FinishedSurface& place) {
     RefinementGoal goal = goal_;
-    goal.way = chance_.below(2) == 0 ? 0 : static_cast<int>(chance_.below(static_cast<std::size_t>(refinement_ways())));
+    goal.way = way_of_try();
     goal.most_vertices = std::min(most_in(excerpt, place, goal.most_vertices),
                                   static_cast<std::size_t>(kMostVertices * static_cast<double>(excerpt.vertex.size())));
     return goal;

@@ -20,5 +20,7 @@ struct RefinementWay {
 /// The first is the usual one.
 const RefinementWay& refinement_way(int number);
 int refinement_ways();
+/// Those that divide edges where the boundary bends sharply.
+inline constexpr int kWaysAtKinks[] = {8, 9};
 
 }  // namespace vmesh
