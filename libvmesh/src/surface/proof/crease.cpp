@@ -25,13 +25,14 @@ WallPlane plane_of(const BoundaryPoint& at, const Vec3& p) {
   return {at.sample.distance / slope + normal.dot(p - at.position), normal};
 }
 
-// Moves p the shortest way to both planes. Returns whether they are planes of two walls.
-bool move_to_both(const WallPlane& a, const WallPlane& b, Vec3& p) {
-  const double cosine = a.normal.dot(b.normal), divisor = 1 - cosine * cosine;
-  if (cosine > kCrease || divisor < 1e-3) return false;
-  p -=
-      (a.distance - cosine * b.distance) / divisor * a.normal + (b.distance - cosine * a.distance) / divisor * b.normal;
-  return true;
+// Whether these are of two walls.
+bool are_two(const WallPlane& a, const WallPlane& b) { return a.normal.dot(b.normal) < kCrease; }
+
+// The shortest way from p to both planes.
+Vec3 way_to_both(const WallPlane& a, const WallPlane& b) {
+  const double cosine = a.normal.dot(b.normal), divisor = std::max(1e-3, 1 - cosine * cosine);
+  return -((a.distance - cosine * b.distance) / divisor * a.normal +
+           (b.distance - cosine * a.distance) / divisor * b.normal);
 }
 
 }  // namespace
@@ -82,18 +83,21 @@ std::optional<BoundaryPoint> onto_kink(const VesselField& field, const BoundaryP
                                        double limit) {
   const Vec3 middle = 0.5 * (a.position + b.position);
   const double reach = (a.position - b.position).norm();
-  BoundaryPoint at_a = a, at_b = b;
+  const auto beside = [&](const Vec3& p, const BoundaryPoint& end, double share) {
+    const Vec3 q = p + share * (end.position - p);
+    return plane_of({q, field.sample(q, end.sample.cone)}, p);
+  };
   Vec3 p = middle;
   double share = 1;
-  for (int step = 0; step < kNewtonSteps; ++step) {
-    if (!move_to_both(plane_of(at_a, p), plane_of(at_b, p), p) || (p - middle).norm() > reach) return std::nullopt;
-    const FieldSample s = field.sample(p, a.sample.cone);
-    if (step > 0 && std::abs(distance_by_slope(s)) < 0.1 * limit) return BoundaryPoint{p, s};
-    share *= kNearer;
-    at_a.position = p + share * (a.position - p);
-    at_b.position = p + share * (b.position - p);
-    at_a.sample = field.sample(at_a.position, a.sample.cone);
-    at_b.sample = field.sample(at_b.position, b.sample.cone);
+  for (int step = 0; step < kNewtonSteps; ++step, share *= kNearer) {
+    const WallPlane first = beside(p, a, share), second = beside(p, b, share);
+    if (!are_two(first, second)) return std::nullopt;
+    if (step > 0 && std::max(std::abs(first.distance), std::abs(second.distance)) < 0.1 * limit) {
+      const FieldSample s = field.sample(p, a.sample.cone);
+      if (std::abs(distance_by_slope(s)) < 0.1 * limit) return BoundaryPoint{p, s};
+    }
+    p += way_to_both(first, second);
+    if ((p - middle).norm() > reach) return std::nullopt;
   }
   return std::nullopt;
 }
