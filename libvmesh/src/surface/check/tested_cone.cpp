@@ -8,9 +8,7 @@ namespace {
 
 // Bound on how much the radius of the touching sphere changes per distance moved: the tangent of the cone's half angle.
 double radius_slope(double first, double last, double length) {
-  const double change = std::abs(last - first);
-  if (change >= length) return 0;  // one end contains the other: its sphere touches everywhere
-  const double sine = change / length;
+  const double sine = std::abs(last - first) / length;
   return sine / std::sqrt(1 - sine * sine);
 }
 
@@ -24,7 +22,7 @@ TestedCone::TestedCone(const ConeRelations& relations, Index cone)
       first(relations.axis_point(cone, 0)),
       axis(relations.axis_point(cone, 1) - first),
       length(axis.norm()),
-      slope(radius_slope(shape.r0, shape.r1, length)),
+      slope(is_ball() ? 0 : radius_slope(shape.r0, shape.r1, length)),
       first_share(relations.rounding_of(first_node)),
       last_share(relations.rounding_of(last_node)) {}
 
@@ -34,7 +32,7 @@ std::optional<Fold> fold_between(const TestedCone& a, const TestedCone& b) {
       if ((at_first_of_a ? a.first_node : a.last_node) != (at_first_of_b ? b.first_node : b.last_node)) continue;
       const double way_a = at_first_of_a ? 1 : -1, way_b = at_first_of_b ? 1 : -1;  // away from the node
       const double widening_a = way_a * (a.shape.r1 - a.shape.r0), widening_b = way_b * (b.shape.r1 - b.shape.r0);
-      if (std::abs(widening_a) >= a.length || std::abs(widening_b) >= b.length) continue;
+      if (a.is_ball() || b.is_ball()) continue;
       const double cosine = -(way_a * a.axis).dot(way_b * b.axis) / (a.length * b.length);
       const double bend = std::acos(std::clamp(cosine, -1.0, 1.0)) + std::asin(widening_a / a.length) +
                           std::asin(widening_b / b.length);

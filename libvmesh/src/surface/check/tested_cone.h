@@ -10,7 +10,7 @@ namespace vmesh {
 struct TestedCone {
   TestedCone(const ConeRelations& relations, Index cone);
 
-  /// One end contains the other.
+  /// One end contains the other: its sphere touches everywhere.
   bool is_ball() const { return shape.t_low == shape.t_high; }
   double share_at(double t) const { return first_share + t * (last_share - first_share); }
 

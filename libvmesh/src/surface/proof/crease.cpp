@@ -28,11 +28,12 @@ WallPlane plane_of(const BoundaryPoint& at, const Vec3& p) {
 // Whether these are of two walls.
 bool are_two(const WallPlane& a, const WallPlane& b) { return a.normal.dot(b.normal) < kCrease; }
 
-// The shortest way from p to both planes.
-Vec3 way_to_both(const WallPlane& a, const WallPlane& b) {
-  const double cosine = a.normal.dot(b.normal), divisor = std::max(1e-3, 1 - cosine * cosine);
-  return -((a.distance - cosine * b.distance) / divisor * a.normal +
-           (b.distance - cosine * a.distance) / divisor * b.normal);
+// The shortest way to both planes; nothing if they are nearly parallel.
+std::optional<Vec3> way_to_both(const WallPlane& a, const WallPlane& b) {
+  const double cosine = a.normal.dot(b.normal), divisor = 1 - cosine * cosine;
+  if (divisor < 1e-3) return std::nullopt;
+  return Vec3(-((a.distance - cosine * b.distance) / divisor * a.normal +
+                (b.distance - cosine * a.distance) / divisor * b.normal));
 }
 
 }  // namespace
@@ -70,11 +71,9 @@ std::optional<BoundaryPoint> onto_crease(const VesselField& field, const Crease&
       const FieldSample s = field.sample(p, crease.first);
       return std::abs(s.distance) < 0.1 * limit ? std::optional(BoundaryPoint{p, s}) : std::nullopt;
     }
-    // The shortest way to both.
-    const double cosine = a.gradient.dot(b.gradient), divisor = 1 - cosine * cosine;
-    if (divisor < 1e-3) return std::nullopt;
-    p -= (a.distance - cosine * b.distance) / divisor * a.gradient +
-         (b.distance - cosine * a.distance) / divisor * b.gradient;
+    const auto way = way_to_both({a.distance, a.gradient}, {b.distance, b.gradient});
+    if (!way) return std::nullopt;
+    p += *way;
   }
   return std::nullopt;
 }
@@ -96,8 +95,9 @@ std::optional<BoundaryPoint> onto_kink(const VesselField& field, const BoundaryP
       const FieldSample s = field.sample(p, a.sample.cone);
       if (std::abs(distance_by_slope(s)) < 0.1 * limit) return BoundaryPoint{p, s};
     }
-    p += way_to_both(first, second);
-    if ((p - middle).norm() > reach) return std::nullopt;
+    const auto way = way_to_both(first, second);
+    if (!way || (p + *way - middle).norm() > reach) return std::nullopt;
+    p += *way;
   }
   return std::nullopt;
 }
