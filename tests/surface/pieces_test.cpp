@@ -199,15 +199,32 @@ TEST(Pieces, OfAnotherDivisionAreGatheredWithThoseThatStay) {
   EXPECT_TRUE(same(surface, gather(divided.tubes, next, all)));
 }
 
+void collect_points(const VesselRings& tubes, Index branch, std::vector<Vec3>& points) {
+  for (const Ring& ring : tubes.rings(branch)) {
+    for (const RingPoint& p : ring.points) points.push_back(p.position);
+  }
+}
+
+TEST(Rings, AreReleasedByBranch) {
+  Divided divided(testing::plausible_tree(3));
+  const auto branches = static_cast<Index>(divided.tubes.axes().size());
+  ASSERT_GT(branches, 10u);
+  std::vector<std::vector<Vec3>> before(branches);
+  for (Index b = 0; b < branches; ++b) collect_points(divided.tubes, b, before[b]);
+  for (Index b = 0; b < branches; b += 2) divided.tubes.release(b);
+  for (Index b = 1; b < branches; b += 2) {
+    std::vector<Vec3> after;
+    collect_points(divided.tubes, b, after);
+    EXPECT_EQ(before[b], after);
+    EXPECT_TRUE(divided.tubes.rings(b - 1).empty());
+  }
+}
+
 TEST(Rings, AreLaidAgainAsTheyWere) {
   Divided divided(testing::plausible_tree(3));
   std::vector<Vec3> before, after;
   const auto collect = [&](std::vector<Vec3>& points) {
-    for (Index b = 0; b < divided.tubes.axes().size(); ++b) {
-      for (const Ring& ring : divided.tubes.rings(b)) {
-        for (const RingPoint& p : ring.points) points.push_back(p.position);
-      }
-    }
+    for (Index b = 0; b < divided.tubes.axes().size(); ++b) collect_points(divided.tubes, b, points);
   };
   collect(before);
   EXPECT_FALSE(before.empty());

@@ -43,7 +43,7 @@ struct Band {
 // Chooses seams along a branch.
 class SeamSearch {
  public:
-  SeamSearch(const VesselAxes& axes, const GenerateOptions& options, Index branch, const std::vector<Ring>& rings)
+  SeamSearch(const VesselAxes& axes, const GenerateOptions& options, Index branch, std::span<const Ring> rings)
       : field_(axes.field()),
         options_(options),
         proof_(axes.field()),
@@ -52,7 +52,7 @@ class SeamSearch {
         rings_(rings) {}
 
   std::vector<RingPlace> run() {
-    const std::vector<Ring>& rings = rings_;
+    const std::span<const Ring> rings = rings_;
     const BranchAxis& axis = axis_;
     for (std::size_t k = 0; k < rings.size();) {
       if (!rings[k].free) {
@@ -156,7 +156,7 @@ class SeamSearch {
   ErrorProof proof_;
   const BranchAxis& axis_;
   Index branch_;
-  const std::vector<Ring>& rings_;
+  const std::span<const Ring> rings_;
   std::vector<RingPlace> seams_;
 };
 
@@ -303,7 +303,7 @@ RingCounts::RingCounts(const VesselRings& tubes) : centerline_(tubes.centerline(
 }
 
 std::vector<RingPlace> find_seams(const VesselAxes& axes, const GenerateOptions& options, Index branch,
-                                  const std::vector<Ring>& rings) {
+                                  std::span<const Ring> rings) {
   return SeamSearch(axes, options, branch, rings).run();
 }
 

@@ -55,7 +55,7 @@ struct Division {
 /// make it, so that keeping them as they are costs nothing. They lie about halfway between two junctions, with more of
 /// them along long runs. A ring at which the options ask for refinement is not a seam.
 std::vector<RingPlace> find_seams(const VesselAxes& axes, const GenerateOptions& options, Index branch,
-                                  const std::vector<Ring>& rings);
+                                  std::span<const Ring> rings);
 
 /// Divides a surface at these seams.
 Division divide(const RingCounts& rings, std::vector<RingPlace> seams);

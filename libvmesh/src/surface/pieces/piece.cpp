@@ -156,7 +156,7 @@ class PieceMaker {
   // Where very many vessels part, the rounding between them ends in webs just where the first rings are free.
   void leave_room_at_hubs() {
     for (const Stretch& stretch : plan_.stretches) {
-      const std::vector<Ring>& rings = tubes_.rings(stretch.branch);
+      const std::span<const Ring> rings = tubes_.rings(stretch.branch);
       const std::vector<Index>& nodes = tubes_.axes()[stretch.branch].branch().nodes;
       for (const bool at_end : {false, true}) {
         if (at_end ? stretch.seam_at_last : stretch.seam_at_first) continue;
@@ -186,7 +186,7 @@ class PieceMaker {
       for (const PieceFault& fault : faults) calm_spots_.push_back({fault.position, kCalm * fault.radius});
     }
     for (const Stretch& stretch : plan_.stretches) {
-      const std::vector<Ring>& rings = tubes_.rings(stretch.branch);
+      const std::span<const Ring> rings = tubes_.rings(stretch.branch);
       for (Index k = 0; k < stretch.count; ++k) {
         const auto number = static_cast<Index>((stretch.first + k) % rings.size());
         const Ring& ring = rings[number];
@@ -306,7 +306,7 @@ class PieceMaker {
   double length_in_radii() const {
     double rings = 0;  // if they lay evenly
     for (const Stretch& stretch : plan_.stretches) {
-      const std::vector<Ring>& all = tubes_.rings(stretch.branch);
+      const std::span<const Ring> all = tubes_.rings(stretch.branch);
       for (Index k = 0; k < stretch.count; ++k) rings += all[(stretch.first + k) % all.size()].elongation;
     }
     return (rings + 2 * static_cast<double>(plan_.nodes.size())) * RingOptions::of(context_.options).pitch();

@@ -1,6 +1,7 @@
 #include "surface/tubes/growth_skeleton.h"
 
 #include <map>
+#include <numeric>
 
 #include <tbb/parallel_for.h>
 
@@ -50,7 +51,7 @@ class SkeletonMaker {
   }
 
   std::vector<Ring> rings_of(const Stretch& stretch, const std::vector<RingPlace>& covered) {
-    const std::vector<Ring>& all = all_rings_.rings(stretch.branch);
+    const std::span<const Ring> all = all_rings_.rings(stretch.branch);
     std::vector<Ring> rings;
     bool changed = false;
     for (Index k = 0; k < stretch.count; ++k) {
@@ -253,34 +254,43 @@ VesselAxes::VesselAxes(const VesselField& field, const RingOptions& rings, std::
       layer_(field, axes_, places_, rings) {}
 
 VesselRings::VesselRings(const VesselField& field, const RingOptions& rings)
-    : VesselAxes(field, rings), elongated_(rings.elongation > 1) {
+    : VesselAxes(field, rings), rings_(axes().size()), elongated_(rings.elongation > 1) {
   lay_all();
 }
 
 VesselRings::VesselRings(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches)
-    : VesselAxes(field, rings, std::move(branches)), elongated_(rings.elongation > 1) {
+    : VesselAxes(field, rings, std::move(branches)), rings_(axes().size()), elongated_(rings.elongation > 1) {
   lay_all();
 }
 
 void VesselRings::lay_all() {
-  rings_.resize(axes().size());
   counts_.resize(axes().size());
-  tbb::parallel_for(std::size_t{0}, rings_.size(), [&](std::size_t b) {
-    rings_[b] = layer().lay(static_cast<Index>(b));
-    counts_[b] = static_cast<Index>(rings_[b].rings.size());
-  });
+  profiles_.resize(axes().size());
+  std::vector<Index> all(axes().size());
+  std::iota(all.begin(), all.end(), Index{0});
+  lay(all);
 }
 
-void VesselRings::release(Index branch) {
-  std::vector<Ring>().swap(rings_[branch].rings);
-  std::vector<RingPoint>().swap(rings_[branch].points);
+void VesselRings::lay(std::span<const Index> branches) {
+  while (!branches.empty()) {
+    const auto block = branches.first(std::min(branches.size(), RingBlocks::kBranches));
+    std::vector<Rings> laid(block.size());
+    tbb::parallel_for(std::size_t{0}, block.size(), [&](std::size_t i) { laid[i] = layer().lay(block[i]); });
+    rings_.add(block, laid);
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      counts_[block[i]] = static_cast<Index>(laid[i].rings.size());
+      profiles_[block[i]] = std::move(laid[i].elongation);
+    }
+    branches = branches.subspan(block.size());
+  }
 }
 
 void VesselRings::lay_again(const std::vector<Index>& branches) {
-  tbb::parallel_for(std::size_t{0}, branches.size(), [&](std::size_t i) {
-    Rings& rings = rings_[branches[i]];
-    if (rings.rings.empty()) rings = layer().lay(branches[i]);
-  });
+  std::vector<Index> released;
+  for (const Index b : branches) {
+    if (rings(b).empty()) released.push_back(b);
+  }
+  lay(released);
 }
 
 Elongation VesselRings::elongation_at(Index cone, double t) const {
@@ -288,7 +298,7 @@ Elongation VesselRings::elongation_at(Index cone, double t) const {
   const auto [branch, nth] = place_of(cone);
   const BranchAxis& axis = axes()[branch];
   const double place = axis.place_of(nth, t);
-  const double times = rings_[branch].elongation.at(axis.radii_of(place));
+  const double times = profiles_[branch].at(axis.radii_of(place));
   if (times <= 1) return {};
   return {times, layer().direction_at(branch, place)};
 }

@@ -5,7 +5,7 @@
 
 #include "vmesh/surface/part.h"
 
-#include "surface/tubes/vessel_rings.h"
+#include "surface/tubes/ring_blocks.h"
 
 namespace vmesh {
 
@@ -43,10 +43,10 @@ class VesselRings : public VesselAxes, public ElongationField {
   VesselRings(const VesselField& field, const RingOptions& rings, std::vector<Branch> branches);
 
   /// None while they are released.
-  const std::vector<Ring>& rings(Index branch) const { return rings_[branch].rings; }
+  std::span<const Ring> rings(Index branch) const { return rings_.of(branch); }
   Index ring_count(Index branch) const { return counts_[branch]; }
   /// Frees the rings of a branch. What elongation_at() needs stays.
-  void release(Index branch);
+  void release(Index branch) { rings_.release(branch); }
   /// Lays those that were released, as they were; `branches`: different ones.
   void lay_again(const std::vector<Index>& branches);
   Elongation elongation_at(Index cone, double t) const override;
@@ -57,9 +57,11 @@ class VesselRings : public VesselAxes, public ElongationField {
 
  private:
   void lay_all();
+  void lay(std::span<const Index> branches);
 
-  std::vector<Rings> rings_;   // of every branch
-  std::vector<Index> counts_;  // of them, released or not
+  RingBlocks rings_;
+  std::vector<Index> counts_;                // rings of every branch, released or not
+  std::vector<ElongationProfile> profiles_;  // likewise
   bool elongated_;
 };
 

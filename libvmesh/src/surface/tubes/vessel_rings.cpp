@@ -98,20 +98,6 @@ CrossSection section_beside(const BranchAxis& axis, const Ring& ring, bool after
   return section_at(axis, after ? ring.radii + ring.step / 2 : ring.radii - ring.step / 2);
 }
 
-void Rings::shrink() {
-  std::size_t count = 0;
-  for (const Ring& ring : rings) count += ring.points.size();
-  std::vector<RingPoint> kept;
-  kept.reserve(count);
-  for (Ring& ring : rings) {
-    const std::size_t first = kept.size();
-    kept.insert(kept.end(), ring.points.begin(), ring.points.end());
-    ring.points = std::span(kept).subspan(first);
-  }
-  points = std::move(kept);
-  rings.shrink_to_fit();
-}
-
 double ring_pitch(int around) { return kPitch * balanced_ring_radius(around) * equilateral_height(around); }
 
 RingLayer::RingLayer(const VesselField& field, const std::vector<BranchAxis>& axes,
@@ -121,9 +107,7 @@ RingLayer::RingLayer(const VesselField& field, const std::vector<BranchAxis>& ax
 Rings RingLayer::lay(Index branch) const {
   std::vector<Vec3> sides;
   Rings even = lay_evenly(branch, sides);
-  Rings laid = options_.elongation > 1 ? spread(branch, even, sides) : std::move(even);
-  laid.shrink();
-  return laid;
+  return options_.elongation > 1 ? spread(branch, even, sides) : std::move(even);
 }
 
 // `sides`: of every ring, from where its angles count.

@@ -46,9 +46,6 @@ struct Rings {
   Rings(Rings&&) = default;
   Rings& operator=(Rings&&) = default;
 
-  /// Gives back memory that was reserved in vain.
-  void shrink();
-
   std::vector<Ring> rings;
   std::vector<RingPoint> points;
   ElongationProfile elongation;
