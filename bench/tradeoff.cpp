@@ -90,7 +90,7 @@ void write_markdown(const std::string& file, const std::vector<TradeoffPoint>& p
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
+  if (argc < 2 || argv[1][0] == '-') {
     std::fprintf(stderr, "usage: bench_tradeoff PREFIX [CENTERLINE]\n");
     return 2;
   }

@@ -148,7 +148,7 @@ class SkeletonMaker {
       if (tube.ends_at_tip) capped_[axis.branch().nodes.back()] = 1;
       bare = {b, tube.rings.back().place, axis.length(), {}};
       bare.docks[0] = {number, true};
-      skeleton_.tubes.push_back(std::move(tube));
+      skeleton_.tubes.push_back(tube);
     }
     const bool closed =
         !skeleton_.tubes.empty() && skeleton_.tubes.back().branch == b && to_end && skeleton_.tubes.back().ends_at_tip;
@@ -180,7 +180,7 @@ class SkeletonMaker {
       Tube tube;
       tube.branch = b;
       tube.rings = free_run(rings, k);
-      skeleton_.tubes.push_back(std::move(tube));
+      skeleton_.tubes.push_back(tube);
     }
     const std::size_t count = skeleton_.tubes.size() - first_tube;
     if (count == 0) bare_.push_back({b, 0, axis.length(), {}});
