@@ -136,7 +136,7 @@ Drawing draw_skeleton(const VesselRings& tubes, const Division& division,
 Drawing draw_rings(const VesselRings& tubes, const Division& division) {
   Drawing drawing;
   for (Index b = 0; b < tubes.axes().size(); ++b) {
-    const std::vector<Ring>& rings = tubes.rings(b);
+    const std::span<const Ring> rings = tubes.rings(b);
     for (Index k = 0; k < rings.size(); ++k) {
       const bool is_seam = std::binary_search(division.seams.begin(), division.seams.end(), RingPlace{b, k});
       const int group = is_seam ? kSeam : rings[k].free ? kTube : kJunction;

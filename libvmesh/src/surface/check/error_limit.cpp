@@ -12,8 +12,8 @@ std::vector<Face> ErrorLimitCheck::unproven_faces(const SweepState& state) {
   const BoundSurface& surface = state.surface;
   std::vector<ErrorProof::Corner> vertices(state.mesh.num_vertices());
   for (const Vertex v : state.mesh.vertices()) {
-    const double radius = surface.radius(v), most = kHighestShell * radius;
-    vertices[v.idx()] = {state.point(v), surface.middle_normal(v), std::min(limit_.at(radius), most), surface[v].cone};
+    const double shell = shell_at(limit_, surface.radius(v));
+    vertices[v.idx()] = {state.point(v), surface.middle_normal(v), shell, surface[v].cone};
   }
   std::vector<Face> faces;
   std::vector<Triangle> triangles;

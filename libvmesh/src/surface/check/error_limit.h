@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "vmesh/surface/error_bound.h"
@@ -10,6 +11,11 @@ namespace vmesh {
 
 /// Radii: beyond, the shell would reach the other side of the vessel; idle 0.35 to 0.7.
 inline constexpr double kHighestShell = 0.5;
+
+/// How far from a vertex on a vessel of that radius the shells of a proof reach, mm.
+inline double shell_at(const ErrorLimit& limit, double radius) {
+  return std::min(limit.at(radius), kHighestShell * radius);
+}
 
 /// Checks a surface under construction against a limit, again and again.
 class ErrorLimitCheck {

@@ -13,6 +13,7 @@
 #include "surface/proof/notches.h"
 #include "surface/proof/place_repair.h"
 #include "surface/proof/refine_to_limit.h"
+#include "surface/proof/refined_proof.h"
 
 namespace vmesh {
 namespace {
@@ -126,8 +127,7 @@ class Finish {
     refused_ += coarsen(surface, tubes_.field(), {options_.max_error, options_.least_vertices}, longest, progress_);
     if (options_.max_error.is_set()) {
       // Faces that were proven by bending their shells are at corners that stay; neighbours may lower their shells.
-      const std::vector<Index> unproven =
-          unproven_faces(surface.mesh, surface.binding, tubes_.field(), options_.max_error);
+      const std::vector<Index> unproven = unproven_of(surface);
       if (unproven.size() > whole_.error.unproven_faces) return;
       whole_.error.unproven_faces = unproven.size();
       whole_.error.unproven_places = places_of(surface.mesh, unproven);
@@ -135,6 +135,37 @@ class Finish {
     static_cast<FinishedSurface&>(whole_.grown.surface) = std::move(surface);
     whole_.grown.crossings = self_intersections(whole_.grown.surface.mesh);
     coarsened_ = true;
+  }
+
+  // Refinement has lower shells than unproven_faces() where the limit is above half a radius, and other normals. With
+  // its shells around what is left it is a proof as well.
+  std::vector<Index> unproven_of(const FinishedSurface& surface) const {
+    const ErrorLimit& limit = options_.max_error;
+    std::vector<Index> faces = unproven_faces(surface.mesh, surface.binding, tubes_.field(), limit);
+    if (faces.size() <= whole_.error.unproven_faces || !surface.openings.empty()) return faces;
+    const FinishedMesh mesh = finished_mesh(surface);
+    const std::vector<char> near = are_near(mesh, std::move(faces));
+    const auto shell = [&](Index v) {
+      const double radius = surface.radius[v];
+      return near[v] ? shell_at(limit, radius) : limit.at(radius);
+    };
+    return RefinedProof(tubes_.field(), true).unproven(mesh, {}, shell, [](Index) { return false; });
+  }
+
+  // For every vertex, whether it is one of these faces or beside one.
+  static std::vector<char> are_near(const FinishedMesh& mesh, std::vector<Index> faces) {
+    std::vector<char> near(mesh.vertices().size(), 0);
+    for (int ring = 0; ring <= 1; ++ring) {
+      std::vector<Index> around;
+      for (const Index f : faces) {
+        for (const Index v : mesh.faces()[f]) {
+          near[v] = 1;
+          around.insert(around.end(), mesh.faces_around(v).begin(), mesh.faces_around(v).end());
+        }
+      }
+      faces = std::move(around);
+    }
+    return near;
   }
 
   Elongation elongation_at(const CenterlineBinding& at) const {

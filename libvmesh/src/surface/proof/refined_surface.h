@@ -40,10 +40,7 @@ class RefinedSurface {
 
   const Vec3& point(Index v) const { return mesh.position(v); }
   Index cone(Index v) const { return mesh.vertex(v).binding.segment; }
-  double limit_at(Index v) const {
-    const double radius = mesh.vertex(v).radius;
-    return std::min(goal_.limit.at(radius), kHighestShell * radius);
-  }
+  double limit_at(Index v) const { return shell_at(goal_.limit, mesh.vertex(v).radius); }
   double limit_of(const MeshEdge& e) const { return std::min(limit_at(e.a), limit_at(e.b)); }
   double limit_of(const Triangle& f) const { return std::min({limit_at(f[0]), limit_at(f[1]), limit_at(f[2])}); }
   double length(const MeshEdge& e) const { return (point(e.a) - point(e.b)).norm(); }
