@@ -206,6 +206,24 @@ TEST_P(NarrowNotch, IsWithinTheLimit) {
   EXPECT_LE(worst_deviation(result, VesselField(centerline, blend), limit_of(relative)), 1);
 }
 
+// Above half the radius of thin vessels, four faces of these are proven with the shells of refinement alone. All of
+// 3,429 vertices were then kept.
+TEST(MaxErrorAndElongation, LeaveOutVerticesWhereTheLimitIsAboveHalfTheRadius) {
+  const std::string file = "liver_portal_centerlines/liverModelPatient1__hepatic1_1.swc";
+  VMESH_NEED_SHARED_DATA(file);
+  const Centerline centerline = load_centerline(testing::shared_data(file)).cleaned.centerline;
+  GenerateOptions options;
+  options.blend = 0;
+  options.around = 5;
+  options.max_error.mm = 0.684656;
+  options.elongation = 16;
+  const GenerateResult result = generate_surface(centerline, options);
+  EXPECT_EQ(result.error.unproven_faces, 0u);
+  EXPECT_TRUE(result.is_sound());
+  EXPECT_LT(result.mesh.vertices.size(), 3 * centerline.nodes().size());
+  EXPECT_LE(worst_deviation(result, VesselField(centerline, 0), options.max_error), 1);
+}
+
 // Two daughters that part at a small angle, the second thinner.
 Centerline narrow_fork(double angle_deg, const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
   const double half = angle_deg / 2 * std::numbers::pi / 180;
