@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
+#include <span>
 
 #include "vmesh/core/error.h"
 #include "vmesh/io/centerline_io.h"

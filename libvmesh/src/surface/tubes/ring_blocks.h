@@ -14,7 +14,7 @@ namespace vmesh {
 /// segments).
 class RingBlocks {
  public:
-  /// Branches that are best added together.
+  /// Branches that are added together: some 200 KB. Not varied.
   static constexpr std::size_t kBranches = 64;
 
   explicit RingBlocks(std::size_t branches) : places_(branches) {}
