@@ -43,7 +43,7 @@ constexpr int kErrorRounds = 14;
 constexpr int kErrorSweeps = 4;  // safe 3 to 6
 // Target lengths from which on edges between rings are split, with more vertices around than kFewAround: with these,
 // the maximum distance is elsewhere (a portal vein at 24 around: .011 radii, .010 with it; at 48 .037 and .004).
-constexpr double kStretched = 1.6;
+constexpr double kStretched = 1.3;
 constexpr int kFewAround = 24;
 constexpr int kStretchRounds = 4;  // each at least halves the longest
 // Of target lengths that a limit asks for where the surface is refined later; and rounds until edges are hardly longer.

@@ -134,14 +134,20 @@ class JunctionDocker {
     docked.unproven = report.unproven.size();
     if (report.tangles == 0) return;
     find_hanging(docked);
+    if (report.hopeless && docked.hanging.empty()) docked.hopeless = spots_of(find_tangles(SweepState(surface_)));
     if (docked.hanging.empty() || may_hang_) docked.crossings = find_crossing_walls(SweepState(surface_)).size();
   }
 
   void find_hanging(DockedJunction& docked) {
     const SweepState state(surface_);
     const std::vector<Vertex> strays = find_strays(state);
-    if (!hangs(state, strays)) return;
-    for (const Vertex v : strays) docked.hanging.push_back({surface_.position(v), surface_.radius(v)});
+    if (hangs(state, strays)) docked.hanging = spots_of(strays);
+  }
+
+  std::vector<BoundSurface::Spot> spots_of(const std::vector<Vertex>& vertices) const {
+    std::vector<BoundSurface::Spot> spots;
+    for (const Vertex v : vertices) spots.push_back({surface_.position(v), surface_.radius(v)});
+    return spots;
   }
 
   void export_to(DockedJunction& docked) const {
@@ -201,7 +207,9 @@ DockedJunction make_docked_junction(const VesselRings& tubes, const GrowthSkelet
                                     bool guarded, bool may_hang, const Progress& progress) {
   const VesselField& field = tubes.field();
   const std::vector<TubeEnd> docks = docks_of(junction);
-  const auto flaws = [](const DockedJunction& p) { return std::tuple(p.crossings, p.tangles, p.unproven); };
+  const auto flaws = [](const DockedJunction& p) {
+    return std::tuple(!p.hopeless.empty(), p.crossings, p.tangles, p.unproven);
+  };
   std::optional<DockedJunction> best;
   const JunctionGrowth growth(field, tubes.axes(), skeleton, junction, options, fine_places, progress);
   // When guarded, refinement for the error limit is left to the whole piece.

@@ -36,6 +36,9 @@ struct DockedJunction {
   /// If it hangs: the vertices off the boundary, too many to be mended, and the vessels' radii there. Growth went
   /// around a hole that the volume has and the graph has not, as where vessels part and are rounded together again.
   std::vector<BoundSurface::Spot> hanging;
+  /// If it does not hang but is too tangled to be refined any further (OptimizeReport::hopeless): the same of its
+  /// tangles.
+  std::vector<BoundSurface::Spot> hopeless;
 };
 
 /// Number of rings at each end of a tube that the junction's surface replaces. The next ring is kept and joins the two.

@@ -202,7 +202,7 @@ class PieceMaker {
     return covered_.size() + fine_spots_.size() + calm_spots_.size() > before || newly_guarded;
   }
 
-  // Where junctions hang on every rung, what guarded steps make of them.
+  // Where junctions hang or are hopeless on every rung, what guarded steps make of them.
   PieceSurface make_hanging() {
     may_hang_ = true;
     std::vector<PieceFault> none;
@@ -211,15 +211,15 @@ class PieceMaker {
     return piece;
   }
 
-  // Nothing where a junction hangs: its vertices off the boundary are the faults then.
-  std::optional<PieceSurface> make(const Rung& rung, std::vector<PieceFault>& hanging) {
+  // Nothing where a junction hangs or is hopeless: its vertices off the boundary or in tangles are the faults then.
+  std::optional<PieceSurface> make(const Rung& rung, std::vector<PieceFault>& unusable) {
     const GrowthSkeleton skeleton = make_growth_skeleton(tubes_, plan_, covered_);
     PieceSurface piece;
     piece.junctions = skeleton.junctions.size();
     piece.tubes = skeleton.tubes.size();
     Assembly assembly(tubes_, plan_, skeleton, context_.open);
     const auto docked = docked_junctions(skeleton, rung.guarded);
-    if (!may_hang_ && list_hanging(docked, hanging)) return std::nullopt;
+    if (!may_hang_ && list_unusable(docked, unusable)) return std::nullopt;
     for (std::size_t j = 0; j < skeleton.junctions.size(); ++j) {
       const Junction& junction = skeleton.junctions[j];
       const DockedJunction& grown = **docked[j];
@@ -258,15 +258,17 @@ class PieceMaker {
     return piece;
   }
 
-  static bool list_hanging(const std::vector<const std::optional<DockedJunction>*>& docked,
-                           std::vector<PieceFault>& faults) {
-    if (std::all_of(docked.begin(), docked.end(), [](const auto* grown) { return (*grown)->hanging.empty(); }))
-      return false;
-    faults.clear();
+  static bool list_unusable(const std::vector<const std::optional<DockedJunction>*>& docked,
+                            std::vector<PieceFault>& faults) {
+    std::vector<PieceFault> found;
     for (const auto* grown : docked) {
-      for (const auto& [position, radius] : (*grown)->hanging)
-        faults.push_back({DefectKind::crossing_faces, position, radius, false});
+      for (const auto* spots : {&(*grown)->hanging, &(*grown)->hopeless}) {
+        for (const auto& [position, radius] : *spots)
+          found.push_back({DefectKind::crossing_faces, position, radius, false});
+      }
     }
+    if (found.empty()) return false;
+    faults = std::move(found);
     return true;
   }
 

@@ -7,8 +7,9 @@
 namespace vmesh {
 namespace {
 
-constexpr std::size_t kStarts = 6;  // places from which a band is tried; idle 4 to 8
-constexpr double kTie = 1 - 1e-9;   // derived: ratio of two values from which on they are equal up to rounding
+constexpr std::size_t kStarts = 6;    // places from which a band is tried; idle 4 to 8
+constexpr double kTie = 1 - 1e-9;     // derived: ratio of two values from which on they are equal up to rounding
+constexpr double kSurely = 1 + 1e-6;  // derived: ratio from which on one is longer, ties on the way included
 
 // Shortest path through the grid of pairs (bottom i, top j) from (0, start) once around both loops.
 class BandSearch {
@@ -16,18 +17,32 @@ class BandSearch {
   BandSearch(std::span<const Vec3> bottom, std::span<const Vec3> top)
       : bottom_(bottom), top_(top), cost_((bottom.size() + 1) * (top.size() + 1)), from_bottom_(cost_.size()) {}
 
-  double run(std::size_t first, std::size_t start) {
+  // Infinite if no path is shorter than `enough`. Pairs that only longer ones lead through are not looked at.
+  double run(std::size_t first, std::size_t start, double enough = kInfinite) {
     first_ = first;
     start_ = start;
+    const double most = kSurely * std::min(enough, greedy_cost());
+    std::size_t begin = 0, end = top_.size() + 1;  // of the pairs worth it in the row before
     for (std::size_t i = 0; i <= bottom_.size(); ++i) {
-      for (std::size_t j = 0; j <= top_.size(); ++j) {
+      std::size_t first_worth = kNoPair, last_worth = 0;
+      double via_top = kInfinite;
+      for (std::size_t j = begin; j <= top_.size(); ++j) {
+        const double via_bottom = i > 0 && j < end ? cost(i - 1, j) : kInfinite;
+        if (j >= end && via_top == kInfinite) break;
         const double edge = i + j == 0 ? 0 : in_step(i, j) ? (low(i) - high(j)).squaredNorm() : kInfinite;
-        const double via_bottom = i > 0 ? cost(i - 1, j) : kInfinite, via_top = j > 0 ? cost(i, j - 1) : kInfinite;
         from_bottom_[at(i, j)] = via_bottom < kTie * via_top;
-        cost_[at(i, j)] = i + j == 0 ? 0 : std::min(via_bottom, via_top) + edge;
+        double here = i + j == 0 ? 0 : std::min(via_bottom, via_top) + edge;
+        if (here > most) here = kInfinite;
+        cost_[at(i, j)] = via_top = here;
+        if (here == kInfinite) continue;
+        first_worth = std::min(first_worth, j);
+        last_worth = j;
       }
+      if (first_worth == kNoPair) return kInfinite;
+      begin = first_worth;
+      end = last_worth + 1;
     }
-    return cost_.back();
+    return end > top_.size() ? cost_.back() : kInfinite;
   }
 
   std::vector<Triangle> faces() const {
@@ -46,6 +61,22 @@ class BandSearch {
 
  private:
   static constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  static constexpr std::size_t kNoPair = std::numeric_limits<std::size_t>::max();
+
+  // Of the path that takes the shorter of both next edges each time.
+  double greedy_cost() const {
+    double sum = 0;
+    for (std::size_t i = 0, j = 0; i < bottom_.size() || j < top_.size();) {
+      const auto edge = [&](std::size_t k, std::size_t l) {
+        return k <= bottom_.size() && l <= top_.size() && in_step(k, l) ? (low(k) - high(l)).squaredNorm() : kInfinite;
+      };
+      const double at_bottom = edge(i + 1, j), at_top = edge(i, j + 1);
+      sum += std::min(at_bottom, at_top);
+      if (sum == kInfinite) return kInfinite;
+      ++(at_bottom < at_top ? i : j);
+    }
+    return sum;
+  }
 
   // Neither loop may be walked all the way around while the other stands still: an edge would occur twice.
   bool in_step(std::size_t i, std::size_t j) const {
@@ -97,7 +128,7 @@ std::vector<Triangle> stitch(std::span<const Vec3> bottom, std::span<const Vec3>
   std::size_t best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (const std::size_t start : nearest_of(top, bottom[first])) {
-    const double cost = search.run(first, start);
+    const double cost = search.run(first, start, least);
     if (cost < kTie * least) {
       least = cost;
       best = start;
