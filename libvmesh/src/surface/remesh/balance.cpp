@@ -13,6 +13,7 @@ constexpr double kMostLift = 0.15;
 constexpr double kBalanced = 0.02, kBalancedWithLimit = 0.003;
 // Share of the gap to another vessel into which a vertex may be lifted; safe 0.24 to 0.49.
 constexpr double kShareOfGap = 0.35;
+constexpr int kAttemptsToMove = 12;  // all the way, or half as far as the one before
 
 // Area of every face and signed distance at its centroid.
 struct FaceErrors {
@@ -82,6 +83,22 @@ bool may_move(const SweepState& state, Vertex v, const BoundaryPoint& target) {
   return state.surface.may_place(v, target.position);
 }
 
+// As far towards `target` as may be: where faces would turn too far, in several steps.
+void move_towards(SweepState& state, Vertex v, const BoundaryPoint& target) {
+  double share = 1;
+  for (int attempt = 0; attempt < kAttemptsToMove; ++attempt) {
+    BoundaryPoint place = target;
+    if (share < 1) {
+      place.position = state.point(v) + share * (target.position - state.point(v));
+      place.sample = state.field.sample_fast(place.position, target.sample.cone);
+    }
+    const bool moves = may_move(state, v, place);
+    if (moves) state.surface.place(v, place.position, place.sample);
+    if (moves && share == 1) return;
+    share = moves ? 1 : share / 2;
+  }
+}
+
 }  // namespace
 
 void balance(SweepState& state, const ErrorLimit& limit) {
@@ -90,8 +107,7 @@ void balance(SweepState& state, const ErrorLimit& limit) {
   update_lifts(state, limit);
   for (const Vertex v : state.mesh.vertices()) {
     if (state.surface.held(v) || strays[v.idx()]) continue;
-    const BoundaryPoint target = state.project(v);
-    if (may_move(state, v, target)) state.surface.place(v, target.position, target.sample);
+    move_towards(state, v, state.project(v));
     state.surface[v].lift = state.surface[v].distance;
   }
 }

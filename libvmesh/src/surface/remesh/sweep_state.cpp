@@ -50,6 +50,17 @@ SweepState::SweepState(BoundSurface& bound_surface)
 
 SweepState::~SweepState() { mesh.remove_property_map(stirred_); }
 
+BoundaryPoint SweepState::project(Vertex v) const {
+  const double lift = surface[v].lift;
+  const BoundaryPoint here = project_to_boundary(field, {point(v), surface.sample(v)}, tolerance(v), lift);
+  const double off = std::abs(here.sample.distance - lift);
+  if (off <= tolerance(v) * surface.radius(v)) return here;
+  Vec3 center = Vec3::Zero();
+  for (const Halfedge h : mesh.halfedges_around_target(mesh.halfedge(v))) center += point(mesh.source(h));
+  const BoundaryPoint there = project(v, center / static_cast<double>(mesh.degree(v)));
+  return std::abs(there.sample.distance - lift) < off ? there : here;
+}
+
 double SweepState::mean_square_edge(Face f) const {
   double mean = 0;
   const auto vertices = corners(f);

@@ -115,10 +115,8 @@ class SweepState {
   BoundaryPoint project(Vertex v, const Vec3& p) const {
     return project_to_boundary(field, p, surface[v].cone, tolerance(v), surface[v].lift);
   }
-  /// Where `v` belongs near its present position.
-  BoundaryPoint project(Vertex v) const {
-    return project_to_boundary(field, {point(v), surface.sample(v)}, tolerance(v), surface[v].lift);
-  }
+  /// Where `v` belongs near its present position; where the field has no slope there, near its neighbours' centroid.
+  BoundaryPoint project(Vertex v) const;
   /// Where the vertex belongs to which `a` and `b` would collapse.
   BoundaryPoint project_middle(Vertex a, Vertex b) const {
     return project_to_boundary(field, 0.5 * (point(a) + point(b)), surface[a].cone, tolerance(a),
