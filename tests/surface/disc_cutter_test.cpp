@@ -1,16 +1,20 @@
 #include "surface/junction/disc_cutter.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include <gtest/gtest.h>
 
 #include "vmesh/mesh/topology.h"
 
+#include "draw.h"
 #include "surface/tubes/stitch.h"
 
 namespace vmesh {
 namespace {
+
+using testing::Draw;
 
 std::vector<Vec3> docked_ring(int count, double radius, double height, double turn = 0) {
   std::vector<Vec3> points;
@@ -77,6 +81,62 @@ TEST(Stitch, MakesEquilateralTrianglesBetweenRingsTurnedHalfAStep) {
   for (const auto& face : stitch(bottom, top)) {
     const auto at = [&](Index i) { return i < 6 ? bottom[i] : top[i - 6]; };
     for (int i = 0; i < 3; ++i) EXPECT_LT((at(face[i]) - at(face[(i + 1) % 3])).norm(), 1.05);
+  }
+}
+
+// Sum of the squared edges across the shortest band from the edge (first, start), of all pairs of vertices.
+double shortest_band(const std::vector<Vec3>& bottom, const std::vector<Vec3>& top, std::size_t first,
+                     std::size_t start) {
+  const std::size_t n = bottom.size(), m = top.size();
+  std::vector<double> cost((n + 1) * (m + 1), std::numeric_limits<double>::infinity());
+  const auto at = [&](std::size_t i, std::size_t j) -> double& { return cost[i * (m + 1) + j]; };
+  at(0, 0) = 0;
+  for (std::size_t i = 0; i <= n; ++i) {
+    for (std::size_t j = 0; j <= m; ++j) {
+      if (i + j == 0 || std::abs(double(i) / double(n) - double(j) / double(m)) >= 0.5) continue;
+      const double edge = (bottom[(first + i) % n] - top[(start + j) % m]).squaredNorm();
+      at(i, j) = edge + std::min(i > 0 ? at(i - 1, j) : 1e300, j > 0 ? at(i, j - 1) : 1e300);
+    }
+  }
+  return at(n, m);
+}
+
+// Of the many pairs of two long loops few are looked at, but never so few that a shorter band is missed.
+TEST(Stitch, IsTheShortestBand) {
+  Draw draw(31);
+  for (const auto& [n, m] : {std::pair(96, 96), {96, 48}, {60, 17}, {7, 90}, {5, 4}}) {
+    for (const double noise : {0.0, 0.02, 0.3}) {
+      SCOPED_TRACE(std::to_string(n) + " to " + std::to_string(m) + ", noise " + std::to_string(noise));
+      auto bottom = docked_ring(n, 1, 0), top = docked_ring(m, 1.1, 0.3, draw.uniform(0, 1));
+      for (auto* loop : {&bottom, &top}) {
+        for (Vec3& p : *loop) p += noise * draw.in_cube(1);
+      }
+      // Squared edges across: every one belongs to two faces.
+      double across = 0;
+      const auto point = [&](Index i) { return i < bottom.size() ? bottom[i] : top[i - bottom.size()]; };
+      for (const Triangle& face : stitch(bottom, top)) {
+        for (int k = 0; k < 3; ++k) {
+          const Index a = face[k], b = face[(k + 1) % 3];
+          if ((a < bottom.size()) != (b < bottom.size())) across += 0.5 * (point(a) - point(b)).squaredNorm();
+        }
+      }
+      // It starts at the vertex that is nearest to the other loop, and there at one of the six nearest.
+      const auto nearest = [&](const Vec3& p) {
+        std::vector<std::pair<double, std::size_t>> order;
+        for (std::size_t j = 0; j < top.size(); ++j) order.emplace_back((top[j] - p).squaredNorm(), j);
+        std::sort(order.begin(), order.end());
+        return order;
+      };
+      std::size_t first = 0;
+      for (std::size_t i = 1; i < bottom.size(); ++i) {
+        if (nearest(bottom[i])[0].first < (1 - 1e-9) * nearest(bottom[first])[0].first) first = i;
+      }
+      double shortest = std::numeric_limits<double>::infinity();
+      const auto order = nearest(bottom[first]);
+      for (std::size_t k = 0; k < std::min<std::size_t>(6, order.size()); ++k)
+        shortest = std::min(shortest, shortest_band(bottom, top, first, order[k].second));
+      EXPECT_NEAR(across, shortest, 1e-8 * shortest);
+    }
   }
 }
 
