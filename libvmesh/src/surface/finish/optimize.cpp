@@ -42,9 +42,9 @@ constexpr int kMostLiftDropRounds = 4;  // idle 3 to 6
 constexpr int kErrorRounds = 14;
 constexpr int kErrorSweeps = 4;  // safe 3 to 6
 // Target lengths from which on edges between rings are looked at, with more vertices around than kFewAround, and split
-// where they are as long as others that are. Measured at 96 around: with 1.6, where half of it all goes into triangles
-// that nothing but a split makes better, three liver trees and tree119 have maximum skewness .28 to .35 (with this .25
-// to .30), mean skewness 1.5 to 8 % greater, and .3 % fewer vertices (tree119: 2 %).
+// where they are as long as others that are. Measured at 96 around: with 1.6, where two fifths of the time go into
+// triangles that nothing but a split makes better, three liver trees and tree119 have maximum skewness .28 to .35 (with
+// this .25 to .27), mean skewness 1 to 8 % greater, and at most .4 % fewer vertices (tree119: 2 %). 1.2 gives the same.
 constexpr double kStretched = 1.3;
 constexpr int kFewAround = 24;
 constexpr int kStretchRounds = 4;  // each at least halves the longest

@@ -14,7 +14,8 @@ constexpr double kBalanced = 0.02, kBalancedWithLimit = 0.003;
 // Share of the gap to another vessel into which a vertex may be lifted; safe 0.24 to 0.49.
 constexpr double kShareOfGap = 0.35;
 // All the way, or half as far as the one before. Measured on tree1560 at 96 around, blend .5: with one attempt and
-// without the neighbours' centroid (SweepState::project), a vertex near a saddle of the field is .008 radii off.
+// without the neighbours' centroid (SweepState::project), a vertex near a saddle of the field is .008 radii off. Not
+// varied.
 constexpr int kAttemptsToMove = 12;
 
 // Area of every face and signed distance at its centroid.

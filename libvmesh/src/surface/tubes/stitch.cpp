@@ -72,7 +72,7 @@ class BandSearch {
       };
       const double at_bottom = edge(i + 1, j), at_top = edge(i, j + 1);
       sum += std::min(at_bottom, at_top);
-      if (sum == kInfinite) return kInfinite;
+      if (!(sum < kInfinite)) return kInfinite;  // nor for ever where a place is not a number
       ++(at_bottom < at_top ? i : j);
     }
     return sum;
