@@ -514,7 +514,7 @@ TEST(MeasureRounding, IsTheDistanceOfTheRoundedBoundaryFromThePlainOne) {
   const Centerline centerline = testing::fork();
   const GenerateResult result = generate_surface(centerline);
   const VesselField rounded(centerline, 0.5), plain(centerline);
-  const Deviation measured = measure_rounding(result.mesh, result.binding, rounded, plain, 1);
+  const Deviation measured = measure_rounding(result.mesh, result.binding, rounded, 1);
   // The farthest of the same sample points, found by Newton steps of our own and a query over all cones.
   double farthest = 0;
   for (const auto& [a, b, c] : result.mesh.faces) {
@@ -532,7 +532,7 @@ TEST(MeasureRounding, IsTheDistanceOfTheRoundedBoundaryFromThePlainOne) {
   }
   EXPECT_GT(farthest, 0.01);                     // the crotch is rounded
   EXPECT_NEAR(measured.max_mm, farthest, 1e-5);  // projections end within 1e-6 radii of the boundary
-  const Deviation again = measure_rounding(result.mesh, result.binding, rounded, plain, 2);
+  const Deviation again = measure_rounding(result.mesh, result.binding, rounded, 2);
   EXPECT_EQ(measured.mean_mm, again.mean_mm);
   EXPECT_EQ(measured.max_mm, again.max_mm);
 }

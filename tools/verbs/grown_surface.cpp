@@ -6,8 +6,6 @@
 #include <sstream>
 #include <utility>
 
-#include <tbb/parallel_invoke.h>
-
 #include "vmesh/core/memory.h"
 #include "vmesh/core/text.h"
 #include "vmesh/mesh/patch_names.h"
@@ -116,16 +114,12 @@ void measure_distance(GenerateReport& report, const Centerline& grown) {
   stop_if_interrupted();
   const GenerateOptions& options = report.arguments->production.growth;
   release_freed_memory();
-  std::optional<VesselField> field, plain;
-  const bool with_rounding = !report.arguments->common.json.empty();  // reported there only
-  tbb::parallel_invoke([&] { field.emplace(grown, options.blend); },
-                       [&] {
-                         if (with_rounding) plain.emplace(grown);
-                       });
-  report.deviation = measure_deviation(result.mesh, result.binding, *field, options.threads);
-  if (with_rounding) report.rounding = measure_rounding(result.mesh, result.binding, *field, *plain, options.threads);
-  field.reset();
-  plain.reset();
+  {
+    const VesselField field(grown, options.blend);
+    report.deviation = measure_deviation(result.mesh, result.binding, field, options.threads);
+    if (!report.arguments->common.json.empty())  // reported there only
+      report.rounding = measure_rounding(result.mesh, result.binding, field, options.threads);
+  }
   release_freed_memory();
   stop_if_interrupted();
 }

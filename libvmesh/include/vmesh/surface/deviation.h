@@ -26,9 +26,9 @@ struct Deviation {
 Deviation measure_deviation(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
                             const VesselField& field, int threads = 0);
 
-/// How far the rounding at branches moves the boundary: |signed distance| to the plain union `plain` at points of the
-/// boundary of `rounded` near the same sample points of `mesh`. Both fields are of the same centerline.
+/// How far the rounding at branches moves the boundary: |signed distance| to the plain union of the same cones at
+/// points of the boundary of `rounded` near the same sample points of `mesh`.
 Deviation measure_rounding(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
-                           const VesselField& rounded, const VesselField& plain, int threads = 0);
+                           const VesselField& rounded, int threads = 0);
 
 }  // namespace vmesh

@@ -91,12 +91,10 @@ Deviation measure_deviation(const TriMesh& mesh, const std::vector<CenterlineBin
 }
 
 Deviation measure_rounding(const TriMesh& mesh, const std::vector<CenterlineBinding>& binding,
-                           const VesselField& rounded, const VesselField& plain, int threads) {
-  return gather(mesh, binding, plain, threads, [&](const Vec3& p, Index hint) {
+                           const VesselField& rounded, int threads) {
+  return gather(mesh, binding, rounded, threads, [&](const Vec3& p, Index hint) {
     const BoundaryPoint point = project_to_boundary(rounded, p, hint);
-    // Where nothing is rounded, the nearest cone is as near without rounding: fewer cones are local then.
-    const FieldSample nearest = rounded.sample_cone(point.position, point.sample.cone);
-    return nearest.distance == point.sample.distance ? nearest : plain.sample(point.position, point.sample.cone);
+    return rounded.sample_cone(point.position, point.sample.cone);
   });
 }
 

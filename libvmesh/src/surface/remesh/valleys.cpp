@@ -11,7 +11,7 @@ namespace {
 
 // How much of a valley edges may leave open, relative to what they cut off around a vessel; and the least factor on
 // edges for that.
-constexpr double kOpenInValleys = 1.5, kLeastInValleys = 0.3;
+constexpr double kOpenInValleys = 1.5, kLeastInValleys = 0.12;
 
 class Valleys {
  public:
