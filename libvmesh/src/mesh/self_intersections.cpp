@@ -7,6 +7,7 @@
 #include "vmesh/mesh/face_pair.h"
 #include "vmesh/mesh/topology.h"
 
+#include "mesh/blocks.h"
 #include "mesh/close_faces.h"
 
 namespace vmesh {
@@ -108,14 +109,21 @@ std::vector<std::pair<Index, Index>> self_intersections(const TriMesh& mesh) {
 
 std::vector<std::pair<Index, Index>> intersections_between(const TriMesh& mesh, std::span<const Index> first_face) {
   const PartBoxes boxes(mesh, first_face);
-  std::vector<Index> faces, parts;
-  Index part = 0;
-  for (const Index f : faces_with_area(mesh)) {
-    while (part + 1 < first_face.size() && first_face[part + 1] <= f) ++part;
-    if (!boxes.reaches_others(mesh, f, part)) continue;
-    faces.push_back(f);
-    parts.push_back(part);
-  }
+  const auto part_of = [&](Index f) {
+    const auto next = std::upper_bound(first_face.begin(), first_face.end(), f);
+    return static_cast<Index>(std::max(next, first_face.begin() + 1) - first_face.begin() - 1);
+  };
+  const std::vector<Index> all = faces_with_area(mesh);
+  std::vector<Index> faces =
+      joined_lists(of_blocks<std::vector<Index>>(all.size(), [&](std::size_t i, std::size_t end) {
+        std::vector<Index> reaching;
+        for (; i < end; ++i) {
+          if (boxes.reaches_others(mesh, all[i], part_of(all[i]))) reaching.push_back(all[i]);
+        }
+        return reaching;
+      }));
+  std::vector<Index> parts;
+  for (const Index f : faces) parts.push_back(part_of(f));
   return intersecting(mesh, CloseFaces(mesh, std::move(faces), std::move(parts)));
 }
 

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include "vmesh/core/ascending.h"
 #include "vmesh/core/box_tree.h"
@@ -16,12 +20,14 @@ constexpr double kSphereStep = 0.5;  // mean radii between two spheres that repr
 constexpr double kMostSpheres = 200;
 constexpr double kRoundingInBoxes = 16 * std::numeric_limits<double>::epsilon();  // relative to coordinates
 
+constexpr std::size_t kBlock = 4096;  // cones visited one after the other; each takes a mark of every cone
+
 using Lists = std::vector<std::vector<Index>>;
+using Pairs = std::vector<std::pair<Index, Index>>;
 
 class RoundedOver {
  public:
-  explicit RoundedOver(const ConeRelations& relations)
-      : relations_(relations), added_(relations.cone_count()), mark_(relations.cone_count(), kNone) {
+  explicit RoundedOver(const ConeRelations& relations) : relations_(relations), added_(relations.cone_count()) {
     cones_.reserve(relations.cone_count());
     const Centerline& centerline = relations.centerline();
     for (Index c = 0; c < relations.cone_count(); ++c)
@@ -30,14 +36,12 @@ class RoundedOver {
   }
 
   // What is added for one cone may make others reach it, so the cones next to it are visited again.
-  std::vector<std::pair<Index, Index>> find() {
+  Pairs find() {
     std::vector<Index> visited(cones_.size());
     for (Index c = 0; c < cones_.size(); ++c) visited[c] = c;
-    std::vector<std::pair<Index, Index>> all;
+    Pairs all;
     while (!visited.empty()) {
-      std::vector<std::pair<Index, Index>> found;
-      for (const Index c : visited) visit(c, found);
-      sort_unique(found);
+      const Pairs found = visit_all(visited);
       visited.clear();
       for (const auto& [c, j] : found) {
         added_[c].push_back(j);
@@ -60,6 +64,30 @@ class RoundedOver {
     Vec3 gradient;
   };
 
+  // What it takes to visit cones one after the other.
+  struct Visitor {
+    std::vector<Index> mark;  // of every cone, that for which it was seen last
+    std::vector<Index> others;
+    std::vector<Near> near;
+    Pairs found;
+  };
+
+  // Isolated: a thread that waits for others does not start on a piece of a growing surface.
+  Pairs visit_all(const std::vector<Index>& cones) const {
+    std::vector<Pairs> blocks((cones.size() + kBlock - 1) / kBlock);
+    const auto visit_block = [&](std::size_t b) {
+      Visitor visitor;
+      visitor.mark.assign(cones_.size(), kNone);
+      for (std::size_t i = b * kBlock; i < std::min(cones.size(), (b + 1) * kBlock); ++i) visit(cones[i], visitor);
+      blocks[b] = std::move(visitor.found);
+    };
+    tbb::this_task_arena::isolate([&] { tbb::parallel_for(std::size_t{0}, blocks.size(), visit_block); });
+    Pairs found;
+    for (const Pairs& some : blocks) found.insert(found.end(), some.begin(), some.end());
+    sort_unique(found);
+    return found;
+  }
+
   template <class Visit>
   void for_local(Index c, Visit&& visit) const {
     for (const Index i : relations_.local_cones(c)) visit(i);
@@ -76,46 +104,47 @@ class RoundedOver {
     return {cone.origin.cwiseMin(end).array() - around, cone.origin.cwiseMax(end).array() + around};
   }
 
-  void visit(Index c, std::vector<std::pair<Index, Index>>& found) {
-    for_local(c, [&](Index i) { mark_[i] = c; });
-    others_.clear();
+  void visit(Index c, Visitor& visitor) const {
+    std::vector<Index>&mark = visitor.mark, &others = visitor.others;
+    for_local(c, [&](Index i) { mark[i] = c; });
+    others.clear();
     const BoxTree::Box box = box_of(c, 0);
     tree_.visit_overlapping(box.low, box.high, [&](Index j) {
-      if (mark_[j] == c) return;
+      if (mark[j] == c) return;
       bool meet = false;
-      for_local(j, [&](Index i) { meet = meet || mark_[i] == c; });
-      if (meet && !apart(c, j)) others_.push_back(j);
+      for_local(j, [&](Index i) { meet = meet || mark[i] == c; });
+      if (meet && !apart(c, j)) others.push_back(j);
     });
-    if (!others_.empty()) {
+    if (!others.empty()) {
       const RoundCone& cone = cones_[c];
       const double spheres = std::ceil(cone.axis.norm() / (kSphereStep * cone.radius_at(0.5)));
       const double count = std::clamp(spheres, 1.0, kMostSpheres);
-      for (double k = 0; k <= count && !others_.empty(); ++k) visit_sphere(c, k / count, found);
+      for (double k = 0; k <= count && !others.empty(); ++k) visit_sphere(c, k / count, visitor);
     }
-    for_local(c, [&](Index i) { mark_[i] = kNone; });
+    for_local(c, [&](Index i) { mark[i] = kNone; });
   }
 
-  void visit_sphere(Index c, double t, std::vector<std::pair<Index, Index>>& found) {
+  void visit_sphere(Index c, double t, Visitor& visitor) const {
     const Vec3 p = cones_[c].origin + t * cones_[c].axis;
     const double radius = cones_[c].radius_at(t);
-    bool is_known = false;  // near_
-    std::erase_if(others_, [&](Index j) {
+    bool is_known = false;  // what is near
+    std::erase_if(visitor.others, [&](Index j) {
       const Near other = near_at(p, j);
       if (other.value >= radius + other.reach) return false;
-      if (!is_known) find_near(c, p, radius);
+      if (!is_known) find_near(c, p, radius, visitor.near);
       is_known = true;
-      const bool reaches = std::any_of(near_.begin(), near_.end(), [&](const Near& n) {
+      const bool reaches = std::any_of(visitor.near.begin(), visitor.near.end(), [&](const Near& n) {
         return rounding_reaches(n, other, radius) && !apart(n.cone, j) && are_local(n.cone, j);
       });
-      if (reaches) found.push_back(std::minmax(c, j));
+      if (reaches) visitor.found.push_back(std::minmax(c, j));
       return reaches;
     });
   }
 
-  void find_near(Index c, const Vec3& p, double radius) {
-    near_.clear();
+  void find_near(Index c, const Vec3& p, double radius, std::vector<Near>& near) const {
+    near.clear();
     for_local(c, [&](Index i) {
-      if (const Near n = near_at(p, i); n.value < radius + n.reach) near_.push_back(n);
+      if (const Near n = near_at(p, i); n.value < radius + n.reach) near.push_back(n);
     });
   }
 
@@ -148,9 +177,6 @@ class RoundedOver {
   std::vector<RoundCone> cones_;
   BoxTree tree_;  // of what the blend of a cone reaches
   Lists added_;
-  std::vector<Index> mark_;  // of the cone for which one was seen last
-  std::vector<Index> others_;
-  std::vector<Near> near_;
 };
 
 }  // namespace

@@ -19,6 +19,6 @@ struct LocalityPairs {
 /// vessels whose spheres face only those of their own vessel: pairs of spheres are followed from one to the next, so
 /// related segments lie in one cell, or right at the node. A region consists of consecutive cells along the graph.
 /// `region_size`: least number of segments in a region.
-LocalityPairs segment_locality_by_regions(const Centerline& centerline, double blend, std::size_t region_size = 25'000);
+LocalityPairs segment_locality_by_regions(const Centerline& centerline, double blend, std::size_t region_size = 2'000);
 
 }  // namespace vmesh
