@@ -201,13 +201,16 @@ class Optimizer {
   }
 
   // A bend turns the rings around it, so on its outside they are farther apart than along the vessel, the more so the
-  // finer they are; and shape alone, which knows no size, makes the triangles between them wide as well.
+  // finer they are; and shape alone, which knows no size, makes the triangles between them wide as well. Vertices that
+  // hang over a valley return first: where edges are shorter, a sheet of many hangs there, and none may turn so far
+  // (tree1560 at 96 around, blend .5: .0085 radii off, else .0016).
   void even_out_stretched() {
     for (int round = 0; round < kStretchRounds; ++round) {
       if (state_.field.relations().blend() > 0) {
         make_valleys_finer(state_);
         state_.update_sizes(edge_per_radius_);
       }
+      return_to_boundary(state_);
       if (!touch_stretched(kStretched)) break;
       resize();
     }

@@ -115,6 +115,15 @@ void balance(SweepState& state, const ErrorLimit& limit) {
   }
 }
 
+void return_to_boundary(SweepState& state) {
+  for (const Vertex v : state.mesh.vertices()) {
+    const double off = std::abs(state.surface[v].distance - state.surface[v].lift);
+    if (state.surface.held(v) || off <= arrival_tolerance(state.surface, v) * state.surface.radius(v)) continue;
+    move_towards(state, v, state.project(v));
+    state.stir(v);
+  }
+}
+
 void drop_lifts(SweepState& state, const std::vector<Vertex>& vertices) {
   const auto drop_lift = [&state](Vertex v) {
     if (state.surface.held(v) || state.surface[v].lift <= 0) return;

@@ -12,6 +12,9 @@ namespace vmesh {
 /// nearby. Held vertices stay. Each call comes closer.
 void balance(SweepState& state, const ErrorLimit& limit);
 
+/// Moves vertices that are not at their lifts there, as far as may be.
+void return_to_boundary(SweepState& state);
+
 /// Sets the lifts of these vertices and their neighbours to 0 and moves them back onto the boundary.
 void drop_lifts(SweepState& state, const std::vector<Vertex>& vertices);
 
