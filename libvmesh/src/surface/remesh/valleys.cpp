@@ -10,9 +10,8 @@ namespace vmesh {
 namespace {
 
 // How much of a valley edges may leave open, relative to what they cut off around a vessel; and the least factor on
-// edges for that. Measured on vessel_portal at 48 around: with 0.2 or more, a vertex at the end of the valley between
-// two vessels that part stands .019 radii off, as at 24; 0.12 takes 50 more vertices of 211,000, 0.08 six more.
-constexpr double kOpenInValleys = 1.5, kLeastInValleys = 0.12;
+// edges for that.
+constexpr double kOpenInValleys = 1.5, kLeastInValleys = 0.3;
 
 class Valleys {
  public:
