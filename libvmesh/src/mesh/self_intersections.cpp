@@ -111,7 +111,7 @@ std::vector<std::pair<Index, Index>> intersections_between(const TriMesh& mesh, 
   const PartBoxes boxes(mesh, first_face);
   const auto part_of = [&](Index f) {
     const auto next = std::upper_bound(first_face.begin(), first_face.end(), f);
-    return static_cast<Index>(std::max(next, first_face.begin() + 1) - first_face.begin() - 1);
+    return static_cast<Index>(next - first_face.begin() - 1);
   };
   const std::vector<Index> all = faces_with_area(mesh);
   std::vector<Index> faces =
