@@ -31,6 +31,8 @@ void add_point(std::vector<TradeoffPoint>& points, const Centerline& centerline,
   const auto begin = std::chrono::steady_clock::now();
   const TriMesh mesh = make();
   point.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  std::fprintf(stderr, "\n%s, %s: %.1f s, %zu vertices", curve.c_str(), setting.c_str(), point.seconds,
+               mesh.vertices.size());
   measure_tradeoff_point(point, mesh, centerline);
   points.push_back(point);
 }
@@ -87,6 +89,20 @@ void write_markdown(const std::string& file, const std::vector<TradeoffPoint>& p
   std::fclose(out);
 }
 
+bool tell_percent(std::string_view, double fraction) {
+  static int told = -1;
+  const int percent = static_cast<int>(100 * fraction);
+  if (percent > told) std::fprintf(stderr, "\rvmesh, marching cubes and cones: %d %%", told = percent);
+  return true;
+}
+
+// After each group of curves: a bench of hours that is stopped leaves what it has.
+void write_results(const std::string& prefix, std::vector<TradeoffPoint> points) {
+  mark_best(points);
+  write_markdown(prefix + ".md", points);
+  std::ofstream(prefix + ".svg") << plot_tradeoff(points);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -99,10 +115,10 @@ int main(int argc, char** argv) {
   TradeoffOptions options;
   options.generate.threads = 1;
   options.fine = true;
-  std::vector<TradeoffPoint> points = sweep_tradeoff(centerline, options);
+  std::vector<TradeoffPoint> points = sweep_tradeoff(centerline, options, tell_percent);
+  write_results(prefix, points);
   add_mesh_3(points, centerline);
+  write_results(prefix, points);
   add_related_work(points, centerline);
-  mark_best(points);
-  write_markdown(prefix + ".md", points);
-  std::ofstream(prefix + ".svg") << plot_tradeoff(points);
+  write_results(prefix, points);
 }

@@ -46,7 +46,8 @@ TEST(CrossingGuard, AllowsExactlyWhatCrossesNothingHoweverMuchHasChanged) {
   for (int step = 0; step < 6000; ++step) {
     const Index f = draw.below(static_cast<Index>(flight.faces.size()));
     if (draw.chance(0.1)) {
-      flight.faces[f].reset();  // guards are not told
+      flight.faces[f].reset();
+      guard.touch(f);
       continue;
     }
     const PlacedFace face = Flight::random_face(draw, f);

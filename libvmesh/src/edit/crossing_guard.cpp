@@ -18,6 +18,8 @@ constexpr double kRounding = 1e-15;
 // long.
 constexpr std::size_t kVisitsOfLevel = 2, kVisitsOfFace = 4, kVisitsInVain = 32;
 
+const PlacedFace kNoFace{{kNone, kNone, kNone}, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
+
 BoxTree::Box box_of(const std::array<Vec3, 3>& points) {
   const auto& [a, b, c] = points;
   return {a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)};
@@ -68,16 +70,19 @@ CrossingGuard::CrossingGuard(std::size_t faces, FaceLookup face_at, std::vector<
   }
   axis_tree_ = BoxTree(low, high);
   std::vector<ChangingBoxTree::Item> items;
+  faces_.resize(faces, kNoFace);
   for (Index f = 0; f < faces; ++f) {
-    if (const std::optional<PlacedFace> face = face_at_(f)) items.push_back({f, box_of(face->points)});
+    faces_[f] = face_at_(f).value_or(kNoFace);
+    if (has(f)) items.push_back({f, box_of(faces_[f].points)});
   }
   boxes_ = ChangingBoxTree(items);
 }
 
 void CrossingGuard::touch(Index f) {
-  const std::optional<PlacedFace> face = face_at_(f);
-  if (!face) return;
-  boxes_.set(f, box_of(face->points));
+  if (f >= faces_.size()) faces_.resize(f + std::size_t{1}, kNoFace);
+  faces_[f] = face_at_(f).value_or(kNoFace);
+  if (!has(f)) return;
+  boxes_.set(f, box_of(faces_[f].points));
   if (visited_in_vain_ > kVisitsInVain * boxes_.size()) make_anew();
 }
 
@@ -90,7 +95,7 @@ void CrossingGuard::note_search(std::size_t visited, std::size_t found) const {
 void CrossingGuard::make_anew() {
   std::vector<ChangingBoxTree::Item> items;
   boxes_.visit([&](Index f, const BoxTree::Box& box) {
-    if (face_at_(f)) items.push_back({f, box});
+    if (has(f)) items.push_back({f, box});
   });
   boxes_ = ChangingBoxTree(items);
   visited_in_vain_ = 0;
@@ -114,8 +119,7 @@ bool CrossingGuard::cross_axes(const std::vector<PlacedFace>& faces, const std::
   };
   const auto was_met = [&](Index axis) {
     return std::any_of(gone.begin(), gone.end(), [&](Index f) {
-      const std::optional<PlacedFace> before = face_at_(f);
-      return before && !is_degenerate(*before) && meets(*before, axis);
+      return f < faces_.size() && has(f) && !is_degenerate(faces_[f]) && meets(faces_[f], axis);
     });
   };
   if (faces.empty()) return false;
@@ -142,14 +146,14 @@ bool CrossingGuard::cross_others(const std::vector<PlacedFace>& faces, const std
     const auto is_near = [&](const BoxTree::Box& own) { return own.overlaps(box.low, box.high); };
     const auto first = std::find_if(boxes.begin(), boxes.end(), is_near);
     if (first == boxes.end()) return false;
+    if (!has(f)) return false;
     ++found;
     if (std::find(gone.begin(), gone.end(), f) != gone.end()) return false;
-    const std::optional<PlacedFace> other = face_at_(f);
-    if (!other) --found;
-    if (!other || is_degenerate(*other)) return false;
+    const PlacedFace& other = faces_[f];
     for (auto own = first; own != boxes.end(); ++own) {
       const auto i = static_cast<std::size_t>(own - boxes.begin());
-      if (is_near(*own) && !planes[i].has_on_one_side(*other) && intersect(faces[i], *other)) return true;
+      if (is_near(*own) && !planes[i].has_on_one_side(other) && !is_degenerate(other) && intersect(faces[i], other))
+        return true;
     }
     return false;
   });

@@ -13,7 +13,8 @@
 namespace vmesh {
 
 /// Tells whether a step would make faces of a surface cross each other, or cross an axis line that they did not cross
-/// before. Keeps the boxes of all faces in a tree; faces that are new or have changed must be announced (touch).
+/// before. Keeps all faces, and their boxes in a tree; those that are new, have changed or are removed must be announced
+/// (touch).
 class CrossingGuard {
  public:
   using AxisLine = std::array<Vec3, 2>;
@@ -26,13 +27,14 @@ class CrossingGuard {
   /// Whether faces may be replaced by others.
   bool allows(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const;
 
-  /// The face is new or has changed.
+  /// The face is new, has changed or has been removed.
   void touch(Index f);
 
   /// The steps that were not allowed so far.
   const RefusedSteps& refused() const { return refused_; }
 
  private:
+  bool has(Index f) const { return faces_[f].vertices[0] != kNone; }
   void make_anew();
   // Notes a search for faces that looked at `visited` boxes and found this many.
   void note_search(std::size_t visited, std::size_t found) const;
@@ -41,6 +43,8 @@ class CrossingGuard {
   bool cross_axes(const std::vector<PlacedFace>& faces, const std::vector<Index>& gone) const;
 
   FaceLookup face_at_;
+  // As announced last, by number; a first vertex of kNone: there is none.
+  std::vector<PlacedFace> faces_;
   // Of all faces, and of some that have been removed since.
   ChangingBoxTree boxes_;
   mutable std::size_t visited_in_vain_ = 0;  // boxes, since the tree was made

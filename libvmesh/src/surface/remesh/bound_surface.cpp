@@ -286,7 +286,12 @@ Vertex BoundSurface::split_edge(Edge e) {
 
 Vertex BoundSurface::collapse_edge(Edge e, const BoundaryPoint& target) {
   const BoundVertex one = BoundVertex::merged(vertex_[mesh.vertex(e, 0)], vertex_[mesh.vertex(e, 1)]);
+  const Halfedge h = mesh.halfedge(e);
+  const std::array<Face, 2> beside = {mesh.face(h), mesh.face(mesh.opposite(h))};
   const Vertex v = CGAL::Euler::collapse_edge(e, mesh);
+  for (const Face f : beside) {
+    if (guard_ && f != SurfaceMesh::null_face()) guard_->touch(f.idx());
+  }
   vertex_[v] = one;
   place(v, target.position, target.sample);
   return v;
