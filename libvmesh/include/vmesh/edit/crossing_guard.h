@@ -13,8 +13,8 @@
 namespace vmesh {
 
 /// Tells whether a step would make faces of a surface cross each other, or cross an axis line that they did not cross
-/// before. Keeps all faces, and their boxes in a tree; those that are new, have changed or are removed must be announced
-/// (touch).
+/// before. Keeps all faces, and their boxes in a tree; those that are new, have changed or are removed must be
+/// announced (touch).
 class CrossingGuard {
  public:
   using AxisLine = std::array<Vec3, 2>;
